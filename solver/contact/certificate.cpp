@@ -47,9 +47,9 @@ constexpr double least_force = 3e-9;
 /// The scale of a quantity that is weak relative to others is the geometric mean of both, but at least this
 /// share of the strong one (theory: kkt).
 constexpr double least_share = 1e-3;
-/// Lower limit of the scale relative to the nodal forces of temperature, which balance each other in a freely
-/// expanding body and so are no scale themselves.
-constexpr double least_expansion = 1e-7;
+/// Residuals below this share of the nodal forces of temperature are noise: these forces balance each other
+/// in a freely expanding body, up to a hundred rounding errors. The lower limit of the scale follows from it.
+constexpr double expansion_noise = 1e-13, largest_expansion_share = 1e-3;
 /// Lower limit of a region's force scale, where nothing acts on it: its stiffness times this share of the
 /// largest ratio force / stiffness, a displacement, over all regions.
 constexpr double least_displacement = 1e-8;
@@ -58,6 +58,10 @@ constexpr double least_displacement = 1e-8;
 /// are short sums.
 constexpr double rounding = 1e-15, rounding_of_traces = 3e-16;
 constexpr double tiny = 1e-300;
+
+double least_expansion(double tolerance) {
+  return std::min(largest_expansion_share, expansion_noise / tolerance);
+}
 
 double weak_beside(double weak, double strong, double least = least_share) {
   return std::min(strong, std::max(std::sqrt(weak * strong), least * strong));
@@ -173,6 +177,7 @@ struct BodySums {
   std::vector<RegionSums> of_region;
   std::vector<double> largest;  ///< max |u| of each region
   WholeSums whole;
+  double least_expansion = 0.0;  ///< lower limit of force scales, relative to the nodal forces of temperature
   /// Σ |force| of a region's stresses on nodes of a stiffer one.
   std::map<std::array<std::int32_t, 2>, double> between;  ///< [stiffer, softer]
 };
@@ -219,6 +224,7 @@ BodySums body_sums(const Part& part, const Vector& u, std::span<const double> co
                    const BodyForces& forces, const StiffnessRegions& regions) {
   const std::size_t dim = part.dim();
   BodySums out;
+  out.least_expansion = least_expansion(forces.tolerance);
   out.of_region.resize(regions.count());
   out.largest.resize(regions.count());
   const Vector slanting = slanting_reactions(part, contact, forces);
@@ -333,7 +339,7 @@ Worst judge_equilibrium(const BodySums& body, const Contact& contact, double ela
     const double own = body.of_region.size() == 1 ? 2.0 * elastic * stiffness : 0.0;
     double force = std::sqrt(std::max({s.load, s.reaction, s.spring, s.interface, of_contact, own}));
     const double least =
-        std::max(least_force * stiffness * std::sqrt(s.moved), least_expansion * std::sqrt(s.expansion));
+        std::max(least_force * stiffness * std::sqrt(s.moved), body.least_expansion * std::sqrt(s.expansion));
     const double strong = std::max({force, least, tiny});
     if (weakest < HUGE_VAL) force = weak_beside(weakest, force);
     force = std::max(force, least);
@@ -383,8 +389,9 @@ Worst judge_balance(const Part& part, const BodySums& body, const StiffnessRegio
         s.all += force;
       }
     const double stiffness = s.softness > 0.0 ? s.unknowns / s.softness : 0.0;
-    const double least = std::max({least_force * stiffness * s.moved_all, least_expansion * s.expansion_all,
-                                   stiffness * idle * std::sqrt(s.unknowns)});
+    const double least =
+        std::max({least_force * stiffness * s.moved_all, body.least_expansion * s.expansion_all,
+                  stiffness * idle * std::sqrt(s.unknowns)});
     const double scale = std::max({weak_beside(s.hold, s.all), least, tiny});
     // In axisymmetric bodies the first force component and the moments are balanced by themselves.
     if (is_round) s.unbalanced[0] = 0.0;

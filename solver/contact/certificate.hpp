@@ -44,6 +44,7 @@ struct BodyForces {
   double expansion_energy = 0.0;
   const StiffnessRegions* regions = nullptr;       ///< null: the body is one region
   std::span<const InterfaceForce> interface = {};  ///< StiffnessRegions::interface_forces()
+  double tolerance = 1e-6;                         ///< η of the run
 };
 
 /// Computes the residuals relative to scales of the state, per region and contact entry (theory: kkt,

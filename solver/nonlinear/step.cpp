@@ -130,6 +130,7 @@ Residuals StepContext::certify(std::span<const double> internal, double energy,
   forces.expansion = expansion;
   forces.expansion_energy = expansion_energy;
   forces.regions = &regions;
+  forces.tolerance = options.tolerance;
   const bool counts = !body.linear();
   const auto between = regions.interface_forces(
       state.u, {thermal_pressure, counts ? std::span<const double>(free_strain) : std::span<const double>()},

@@ -268,9 +268,9 @@ sys.exit(1)
     def check(self, **figures):
         with tempfile.TemporaryDirectory() as folder:
             program = pathlib.Path(folder) / "kacanov"
-            program.write_text(self.PROGRAM.format(python=sys.executable, scripts=str(SCRIPTS.resolve()), **figures))
+            program.write_text(self.PROGRAM.format(python=sys.executable, scripts=str((ROOT / "perf").resolve()), **figures))
             program.chmod(0o755)
-            return run("paper/run", program, "--check")
+            return run("perf/paper/run", program, "--check")
 
     def test_the_committed_figures_agree_with_themselves(self):
         done = self.check(r_star=1.005, more=1)
@@ -286,7 +286,7 @@ sys.exit(1)
         self.assertIn("16 smooth 0.005: iterations is", done.stderr)
 
     def test_bad_usage(self):
-        self.assertEqual(run("paper/run", "/nonexistent").returncode, 2)
+        self.assertEqual(run("perf/paper/run", "/nonexistent").returncode, 2)
 
 
 class PenaltyRules(unittest.TestCase):
@@ -311,7 +311,7 @@ count = {{"auto": 10, "osqp": 20, 4.5: 5}}.get(r, 40)
             program = pathlib.Path(folder) / "kacanov"
             program.write_text(self.PROGRAM.format(python=sys.executable))
             program.chmod(0o755)
-            done = run("penalties/run", program, "--case", "*beam2d 16 gap 0 smooth linear", "--tolerance", "1e-6")
+            done = run("perf/penalties/run", program, "--case", "*beam2d 16 gap 0 smooth linear", "--tolerance", "1e-6")
         self.assertEqual(done.returncode, 0, done.stderr)
         rows = {c[2]: c for line in done.stdout.splitlines() if line.startswith("|")
                 for c in [[c.strip() for c in line.split("|")[1:-1]]]}
@@ -321,7 +321,7 @@ count = {{"auto": 10, "osqp": 20, 4.5: 5}}.get(r, 40)
         self.assertEqual(rows["residuals"][3:], ["1", "0", "", "", "", "0"])
 
     def test_bad_usage(self):
-        self.assertEqual(run("penalties/run", "/nonexistent").returncode, 2)
+        self.assertEqual(run("perf/penalties/run", "/nonexistent").returncode, 2)
 
 
 if __name__ == "__main__":

@@ -162,7 +162,7 @@ TEST_CASE("penalties: each rule begins with its own, and only the automatic one 
   const Scales scales{1.0, 1.0, 1.0, 1.0, {}};
   const auto chosen = [&](SolverOptions::Penalty rule) {
     options.penalty = rule;
-    options.r = 7.0;
+    options.r = rule == SolverOptions::Penalty::automatic ? 0.0 : 7.0;
     PenaltyControl control(options, 3.0, usual);
     CHECK(!control.chosen());
     control.choose(5.0, 0.1);

@@ -37,7 +37,7 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
   const std::vector<Row> rows{
       // Unknown keys, with a suggestion where a known key is similar.
       {"solver.tolerence=1",
-       "solver.tolerence: unknown key (did you mean \"tolerance\"?); known here: tolerance,"},
+       "solver.tolerence: unknown key (did you mean \"tolerance\"?); known here: preset, tolerance,"},
       {"meterial=1", "meterial: unknown key (did you mean \"material\"?)"},
       {"contact[0].obstacle.plane.nromal=[0,0,1]",
        "contact[0].obstacle.plane.nromal: unknown key (did you mean \"normal\"?)"},

@@ -24,6 +24,7 @@ ROOT = pathlib.Path(sys.argv.pop()).resolve()
 PROGRAM = sys.argv.pop()
 GUIDE = ROOT / "docs" / "user-guide" / "case-file.md"
 READERS = [ROOT / "tools" / "case" / f"case_{name}.cpp" for name in ("file", "material", "obstacle")]
+READERS.append(ROOT / "tools" / "case" / "preset.cpp")
 VECTOR = [0, 0, 1]
 # A case with every kind of entry; `kacanov check` accepts it except for the missing files.
 SAMPLE = {
@@ -192,10 +193,12 @@ class Cases(unittest.TestCase):
         count = 0
         for room in ("tools", "tests", "perf", "python", "docs"):
             for path in (ROOT / room).rglob("*.json"):
-                case = json.loads(without_comments(path.read_text(encoding="utf-8")))
-                if isinstance(case, dict) and "mesh" in case and "material" in case:
-                    self.assertEqual([error.message for error in self.schema.iter_errors(case)], [], path)
-                    count += 1
+                document = json.loads(without_comments(path.read_text(encoding="utf-8")))
+                within = list(document.values()) if isinstance(document, dict) else document
+                for case in [document, *(within if isinstance(within, list) else [])]:
+                    if isinstance(case, dict) and "mesh" in case and "material" in case:
+                        self.assertEqual([error.message for error in self.schema.iter_errors(case)], [], path)
+                        count += 1
         self.assertGreater(count, 20)
 
     def test_all_snippets_of_the_documents_are_as_it_says(self):

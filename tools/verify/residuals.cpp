@@ -9,7 +9,7 @@
 namespace kacanov::verify {
 namespace {
 
-constexpr Real tiny = 1e-300L, least_force = 3e-9L, least_share = 1e-3L, least_expansion = 1e-7L,
+constexpr Real tiny = 1e-300L, least_force = 3e-9L, least_share = 1e-3L, expansion_noise = 1e-13L,
                least_displacement = 1e-8L, delta = 1e-15L, delta_of_traces = 3e-16L;
 
 /// Returns the slip: u minus its origin, in the free directions orthogonal to the row's normal.
@@ -120,12 +120,14 @@ struct BodySums {
   std::map<std::pair<std::size_t, std::size_t>, Real> between;  ///< forces of softer regions on stiffer ones
   Real residual_work = 0, internal_work = 0, expansion_work = 0, stiff_work = 0;
   Real displacement = 0, supports = 0;
+  Real least_expansion = 0;  ///< lower limit of force scales, relative to the nodal forces of temperature
 };
 
 BodySums sum_body(const Problem& problem, const Regions& regions, const Answer& answer,
                   const BodyResponse& body, const std::vector<Vec>& contact) {
   BodySums sums;
   sums.of_region.resize(regions.bin.size());
+  sums.least_expansion = std::min(1e-3L, expansion_noise / problem.tolerance);
   const auto dim = static_cast<std::size_t>(problem.mesh.dim());
   for (std::size_t n = 0; n < problem.mesh.nodes.size(); ++n) {
     const std::size_t region = regions.of_node[n];
@@ -209,8 +211,8 @@ Worst judge_equilibrium(const Contact& contact, const BodySums& body, Real elast
     const Real outer = larger(larger(s.load, s.reaction), larger(s.spring, square));
     Real force = std::sqrt(larger(outer, larger(s.interface, own)));
     if (weakest < HUGE_VALL) force = weak_beside(weakest, force, least_share);
-    force = larger(force,
-                   larger(least_stiffness(s) * std::sqrt(s.moved), least_expansion * std::sqrt(s.expansion)));
+    force = larger(force, larger(least_stiffness(s) * std::sqrt(s.moved),
+                                 body.least_expansion * std::sqrt(s.expansion)));
     if (s.softness > 0) idle = larger(idle, least_displacement * force * s.softness / s.unknowns);
     scale.push_back(force);
   }
@@ -240,7 +242,7 @@ Worst judge_balance(const Problem& problem, const Regions& regions, const BodySu
     for (const auto& [pair, force] : body.between)
       if (cluster.has[pair.first] && regions.bin[pair.second] > cluster.bin) s.hold += force, s.all += force;
     Real scale = larger(weak_beside(s.hold, s.all, least_share),
-                        larger(least_stiffness(s) * s.moved_all, least_expansion * s.expansion_all));
+                        larger(least_stiffness(s) * s.moved_all, body.least_expansion * s.expansion_all));
     scale = larger(scale, idle * std::sqrt(s.unknowns) * s.unknowns / s.softness);
     Vec moment = s.moment - cross(cluster.centre, s.unbalanced);
     // In axisymmetry the radial force and the moment balance by themselves.
